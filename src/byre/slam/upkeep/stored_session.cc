@@ -117,6 +117,7 @@ std::string fault_of(const StoredSession& session, const StoredMap& map, std::sp
 
 SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Replayed> found, const MapGraph& map) {
   constexpr int kLeastFound = 2;
+  constexpr double kLeastShare = 0.1;    // share of the frames at places that the map shows
   constexpr double kMaxElsewhere = 0.2;  // share of the frames found; one is never enough
   constexpr int kRun = 3;                // successive frames found with the same shift
   constexpr double kSameShift = 0.2;     // metres
@@ -124,13 +125,14 @@ SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Repla
   SessionPlace place;
   place.frames = static_cast<int>(frames.size());
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // shift of the last frame found, metres
-  int run = 0, longest = 0;
+  int run = 0, longest = 0, on_map = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (!found[i].camera_from_world) continue;
     const Pose map_from_camera = inverse(frames[i].camera_from_world);
+    const bool is_on_map = is_mapped(map_from_camera * inverse(frames[i].rig.body_from_camera), mapped);
+    on_map += is_on_map;
+    if (!found[i].camera_from_world) continue;
     const bool is_away = is_elsewhere(frames[i], found[i]);
-    // Keyframes outside the map may be found at places that look alike.
-    if (is_away && !is_mapped(map_from_camera * inverse(frames[i].rig.body_from_camera), mapped)) continue;
+    if (is_away && !is_on_map) continue;  // keyframes outside the map may be found at places that look alike
     ++place.found;
     const Eigen::Vector3d before = shift;
     shift = inverse(*found[i].camera_from_world).translation - map_from_camera.translation;
@@ -142,6 +144,9 @@ SessionPlace place_of(std::span<const ReplayFrame> frames, std::span<const Repla
     place.fault = fmt::format("mapped too little to be placed: it has {} keyframes", place.frames);
   } else if (place.found < kLeastFound) {
     place.fault = fmt::format("is not found in the map: {} of its {} keyframes are", place.found, place.frames);
+  } else if (place.found < kLeastShare * on_map) {
+    place.fault =
+        fmt::format("is not found in the map: {} of its {} keyframes at places of the map are", place.found, on_map);
   } else if (place.elsewhere > std::max(1.0, kMaxElsewhere * place.found) || longest >= kRun) {
     place.fault = fmt::format("contradicts the map: {} of its {} keyframes found are more than 10 cm or 1 degree away",
                               place.elsewhere, place.found);

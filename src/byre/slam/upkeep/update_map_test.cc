@@ -357,5 +357,19 @@ TEST_F(MapUpdates, PlaceASessionByItsKeyframesOnTheMap) {
   EXPECT_THAT(place().fault, HasSubstr("contradicts the map: 3 of its"));
 }
 
+// Two places of a whole mission may be found by chance in a building that has become another.
+TEST_F(MapUpdates, RefuseASessionOfWhichFewKeyframesOnTheMapAreFound) {
+  std::vector<ReplayFrame> frames = frames_to_replay(parent_.stored.map);
+  const std::vector<ReplayFrame> once = frames;
+  while (frames.size() < 50) frames.insert(frames.end(), once.begin(), once.end());
+  std::vector<Replayed> found(frames.size());
+  const auto fault_with = [&](std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) found[i] = {frames[i].camera_from_world, 1e-6 * Matrix6::Identity(), 100};
+    return place_of(frames, found, parent_.stored.map).fault;
+  };
+  EXPECT_THAT(fault_with(2), HasSubstr("is not found in the map: 2 of its"));
+  EXPECT_EQ(fault_with(frames.size() / 10 + 1), "");
+}
+
 }  // namespace
 }  // namespace byre
