@@ -142,9 +142,10 @@ class OfflineTracker {
   // features: receives the features tracked there.
   RivalPlaces::View view_at_rival(const Frame& frame, const Pose& predicted, const Rig& rig, const ImageMask& hidden,
                                   std::vector<int>* features = nullptr) const;
+  // Look-alikes of a place, and those of the places before it until one was certain: shifts at which a building repeats
+  // are not found from each of its places.
   std::span<const LookAlikePlace> look_alikes_at(const Pose& camera_from_place);
-  // shift: from the place to the look-alike, metres.
-  bool is_untestable(const Pose& camera_from_look_alike, double shift) const;
+  bool is_untestable(const Pose& camera_from_look_alike) const;
   std::vector<PointId> points_in_common(const TrackedFrame& tracked);
   void propose_rivals(Timestamp time, const Pose& camera_from_place, std::span<const Pose> rivals, const Rig& rig,
                       const PoseFilter& pose_filter, const Mapper& mapper);
@@ -169,7 +170,8 @@ class OfflineTracker {
   RivalPlaces rivals_;
   ScratchVector<KeyframeId> keyframes_of_look_alikes_;  // keyframes of the last place that was not accepted
   std::vector<int> features_at_rivals_;                 // features of the frame that were tracked at rivals, ascending
-  std::vector<LookAlikePlace> look_alikes_;             // look-alikes of that place
+  std::vector<LookAlikePlace> look_alikes_;             // see look_alikes_at()
+  std::size_t present_look_alikes_ = 0;                 // look-alikes of that place itself, the first ones
   int untestable_ = 0;                                  // look-alike places of the last view_of that cannot be tested
   bool shows_tag_ = false;                              // whether an agreeing tag is in that view
   int frames_since_rivals_ = 0;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace byre {
@@ -102,12 +101,6 @@ ScratchVector<KeyframeId> OfflineMap::keyframes_near(const Pose& camera_from_wor
     nearest.push_back(id);
   }
   return nearest;
-}
-
-double OfflineMap::distance_to_keyframes(const Eigen::Vector3d& camera_in_world) const {
-  double least = std::numeric_limits<double>::infinity();
-  for (const View& view : views_) least = std::min(least, (view.camera_in_world - camera_in_world).norm());
-  return least;
 }
 
 }  // namespace byre

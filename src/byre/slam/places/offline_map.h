@@ -57,8 +57,6 @@ class OfflineMap {
   // Keyframes near a camera with a similar viewing direction, nearest first, by the distance in metres plus the angle
   // between the directions in radians.
   ScratchVector<KeyframeId> keyframes_near(const Pose& camera_from_world, double max_distance, int max_count) const;
-  // Metres from a camera to the nearest keyframe of any direction.
-  double distance_to_keyframes(const Eigen::Vector3d& camera_in_world) const;
 
  private:
   MapGraph map_;

@@ -146,6 +146,17 @@ TEST(PlaceHypothesis, IgnoresPointsSharedWithARival) {
   EXPECT_TRUE(without.is_accepted());
 }
 
+// Points that a look-alike has as well, but that are not seen, are evidence against the place and not for it.
+TEST(PlaceHypothesis, IsNoMoreCertainAgainstARivalThanAgainstAnyPlace) {
+  PlaceView view = view_of_room(10, 0);
+  for (std::size_t i = 0; i < view.cells.size() / 2; ++i) {
+    view.cells[i].seen = view.cells[i].expected_alone = view.cells[i].seen_alone = 0;
+  }
+  PlaceHypothesis place(0.0, 0);
+  place.observe(view, true, 0.0);
+  EXPECT_EQ(place.log_odds_to_rivals(), place.log_odds());
+}
+
 TEST(PlaceHypothesis, StaysAcceptedAfterCellsAreForgotten) {
   PlaceHypothesis place = observed(PlaceHypothesis(-10.0, 0), view_of_room(16, 0), 1);
   ASSERT_TRUE(place.is_accepted());
