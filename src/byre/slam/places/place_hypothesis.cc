@@ -142,8 +142,9 @@ void PlaceHypothesis::observe(const PlaceView& view, bool is_tracked, double log
   std::erase_if(tags_, is_forgotten);
   const double by_others = prior_ + evidence_of_tags();
   log_odds_ = by_others + evidence(&Cell::all);
-  log_odds_to_rivals_ = std::min(log_odds_, by_others + evidence(&Cell::alone));
-  if (is_confirmed() && log_odds_ >= accept_ && log_odds_to_rivals_ - log_odds_of_rivals >= accept_) {
+  log_odds_to_rivals_ = by_others + evidence(&Cell::alone);
+  const double least = std::min(log_odds_, log_odds_to_rivals_);
+  if (is_confirmed() && log_odds_ >= accept_ && least - log_odds_of_rivals >= accept_) {
     is_accepted_ = true;
     prior_ = std::max(prior_, 0.0);  // the cells that outweighed it may be forgotten earlier
   }

@@ -43,7 +43,7 @@ class PlaceHypothesis {
   void require_confirmations(int confirmations) { confirmations_left_ = confirmations; }
 
   double log_odds() const { return log_odds_; }  // against all places but look-alikes
-  // Against a look-alike place, by points that it does not have; at most log_odds().
+  // Against a look-alike place, by points that it does not have.
   double log_odds_to_rivals() const { return log_odds_to_rivals_; }
   // Enough frames were tracked for mapping to use the pose.
   bool is_confirmed() const { return confirmations_left_ == 0; }

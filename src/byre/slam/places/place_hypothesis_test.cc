@@ -147,14 +147,18 @@ TEST(PlaceHypothesis, IgnoresPointsSharedWithARival) {
 }
 
 // Points that a look-alike has as well, but that are not seen, are evidence against the place and not for it.
-TEST(PlaceHypothesis, IsNoMoreCertainAgainstARivalThanAgainstAnyPlace) {
+TEST(PlaceHypothesis, MustOutweighItsRivalsByAllPointsToo) {
   PlaceView view = view_of_room(10, 0);
   for (std::size_t i = 0; i < view.cells.size() / 2; ++i) {
     view.cells[i].seen = view.cells[i].expected_alone = view.cells[i].seen_alone = 0;
   }
+  const double accept = RegistrationOptions{}.accept_log_odds;
   PlaceHypothesis place(0.0, 0);
-  place.observe(view, true, 0.0);
-  EXPECT_EQ(place.log_odds_to_rivals(), place.log_odds());
+  place.observe(view, true, 100.0);
+  ASSERT_GT(place.log_odds_to_rivals(), place.log_odds());
+  const double between = 0.5 * (place.log_odds_to_rivals() + place.log_odds());
+  place.observe(view, true, between - accept);
+  EXPECT_FALSE(place.is_accepted());
 }
 
 TEST(PlaceHypothesis, StaysAcceptedAfterCellsAreForgotten) {
