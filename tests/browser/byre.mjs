@@ -73,6 +73,11 @@ export async function openPage(browser, url, options = {}) {
   return page;
 }
 
+/** Saves the window as screenshots/NAME.png. */
+export function screenshot(page, name) {
+  return page.screenshot({ path: `screenshots/${name}.png` });
+}
+
 /** Violations of the rules of axe on the present page: rule and elements each. */
 export async function accessibilityFaults(page) {
   await page.evaluate(axe.source);

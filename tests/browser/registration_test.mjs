@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { afterEach, beforeEach, describe, test } from "node:test";
 import { Barn, nearest, trueBodies } from "./barn.mjs";
-import { accessibilityFaults, eventually, openPage, outputOf, startBrowser, Viewer } from "./byre.mjs";
+import { accessibilityFaults, eventually, openPage, outputOf, screenshot, startBrowser, Viewer } from "./byre.mjs";
 
 const kPlan = "barn_1/plan/plan.yaml";
 const kZoom = 12; // of the plan and the pictures for a click
@@ -81,7 +81,7 @@ describe("A map and a plan picture", () => {
     await page.getByText(/[56] picks fit, rms/).waitFor();
     const residual = centimetresIn(await page.locator(".fit").innerText());
     await page.getByText(/Next best pick: near the ring/).waitFor();
-    await page.screenshot({ path: "screenshots/registration.png" });
+    await screenshot(page, "registration");
     await page.getByRole("button", { name: "Save the registered map" }).click();
     await page.getByText(/Written: .*barn-plan.byre/).waitFor();
     assert.deepEqual(page.problems, []);
@@ -112,7 +112,7 @@ describe("A map and a plan picture", () => {
       await pick(page, barn, mark, i === 2 ? [mark.world[0] + 1.5, mark.world[1]] : mark.world);
     }
     await page.getByText(/place 3 is wrong: it is off by 1\d\d\.\d cm/).waitFor();
-    await page.screenshot({ path: "screenshots/wrong_pick.png" });
+    await screenshot(page, "wrong_pick");
     await page.getByRole("button", { name: "Remove place 3" }).click();
     await page.getByText(/4 picks fit, rms/).waitFor();
     await eventually(async () => (await page.getByText(/is wrong/).count()) === 0, () => "no wrong pick");
@@ -134,7 +134,7 @@ describe("A map and a plan picture", () => {
     const page = await openMap({ locale: "de-DE" }, "-o", "proposed.byre");
     await page.getByRole("button", { name: "Nach Wänden vorschlagen" }).click();
     await page.getByText(/Vorschlag: Hindernisse auf Wänden: \d+ %/).waitFor();
-    await page.screenshot({ path: "screenshots/proposal.png" });
+    await screenshot(page, "proposal");
     await page.getByRole("button", { name: "Die eingeordnete Karte speichern" }).click();
     const anyway = page.getByRole("button", { name: "Trotzdem speichern" });
     const written = page.getByText(/Geschrieben: .*proposed.byre/);

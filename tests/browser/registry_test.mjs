@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { after, afterEach, before, beforeEach, describe, test } from "node:test";
-import { accessibilityFaults, eventually, openPage, outputOf, startBrowser, Viewer } from "./byre.mjs";
+import { accessibilityFaults, eventually, openPage, outputOf, screenshot, startBrowser, Viewer } from "./byre.mjs";
 
 const kOwner = process.env.PGUSER;
 
@@ -73,7 +73,7 @@ describe("A registry of maps", () => {
       () => page.evaluate(() => document.querySelector("figure.keyframe-picture img").naturalWidth > 100),
       () => "a picture",
     );
-    await page.screenshot({ path: "screenshots/registry_map.png" });
+    await screenshot(page, "registry_map");
     await page.getByRole("link", { name: "Back to the review" }).click();
 
     const accept = page.getByRole("button", { name: "Accept" });
@@ -91,7 +91,7 @@ describe("A registry of maps", () => {
     await page.getByText(`version ${updated} is not proposed`).first().waitFor();
     assert.ok(await accept.isDisabled());
     assert.equal(stateOf(updated), "accepted");
-    await page.screenshot({ path: "screenshots/registry_version.png" });
+    await screenshot(page, "registry_version");
     assert.deepEqual(await accessibilityFaults(page), []);
 
     await page.getByRole("link", { name: "barn", exact: true }).click();
@@ -154,7 +154,7 @@ describe("A registry of maps", () => {
     await page.getByText(/^Floor plan ground 1 \(plan.yaml\), added by ann at 20/).waitFor();
     const loaded = await page.evaluate(() => performance.getEntriesByType("resource").map(({ name }) => name));
     assert.ok(loaded.some((name) => name.includes("/plan.png")), "the picture of the plan");
-    await page.screenshot({ path: "screenshots/registry_plan.png" });
+    await screenshot(page, "registry_plan");
     assert.deepEqual(await accessibilityFaults(page), []);
     assert.deepEqual(page.problems, []);
   });

@@ -1,7 +1,7 @@
 // End-to-end tests of the viewer during a run. Screenshots are written to the folder "screenshots".
 import assert from "node:assert/strict";
 import { afterEach, beforeEach, describe, test } from "node:test";
-import { eventually, openPage, startBrowser, Viewer } from "./byre.mjs";
+import { eventually, openPage, screenshot, startBrowser, Viewer } from "./byre.mjs";
 import { differentPixels, pictureOf, settledPictureOf } from "./pixels.mjs";
 
 const kStage = "#stage > canvas";
@@ -14,10 +14,6 @@ afterEach(async () => {
   await browser.close();
   viewer?.end();
 });
-
-function screenshot(page, name) {
-  return page.screenshot({ path: `screenshots/${name}.png` });
-}
 
 /** ARIA attribute of the timeline; valuenow and valuemax are frame numbers. */
 async function frameOf(page, attribute) {

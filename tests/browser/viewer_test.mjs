@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { existsSync, readFileSync, rmSync } from "node:fs";
 import { afterEach, beforeEach, describe, test } from "node:test";
-import { accessibilityFaults, eventually, openPage, outputOf, startBrowser, Viewer } from "./byre.mjs";
+import { accessibilityFaults, eventually, openPage, outputOf, screenshot, startBrowser, Viewer } from "./byre.mjs";
 import { differentPixels, settledPictureOf } from "./pixels.mjs";
 import { writePlan } from "./plan.mjs";
 
@@ -15,10 +15,6 @@ afterEach(async () => {
   await browser.close();
   viewer?.end();
 });
-
-function screenshot(page, name) {
-  return page.screenshot({ path: `screenshots/${name}.png` });
-}
 
 async function pointCount(page) {
   return Number(await page.locator("#stage").getAttribute("data-points"));

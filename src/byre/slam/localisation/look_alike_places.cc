@@ -116,4 +116,15 @@ std::vector<LookAlikePlace> look_alike_places(const OfflineMap& offline, const P
   return places;
 }
 
+void add_look_alikes(std::span<const LookAlikePlace> more, std::vector<LookAlikePlace>& places) {
+  constexpr std::size_t kMostInAll = 6;  // bounds the time of a frame
+  constexpr double kSameShift = 1.0;     // metres
+  for (const LookAlikePlace& place : more) {
+    const auto is_same = [&](const LookAlikePlace& known) {
+      return std::min((known.shift - place.shift).norm(), (known.shift + place.shift).norm()) <= kSameShift;
+    };
+    if (places.size() < kMostInAll && std::ranges::none_of(places, is_same)) places.push_back(place);
+  }
+}
+
 }  // namespace byre

@@ -2,6 +2,7 @@
 
 #include "byre/slam/places/offline_map.h"
 
+#include <span>
 #include <vector>
 
 namespace byre {
@@ -16,5 +17,8 @@ struct LookAlikePlace {
 // Places that look like the one at a pose: shifts at which many points seen by keyframes near the pose have look-alike
 // points. Most points first.
 std::vector<LookAlikePlace> look_alike_places(const OfflineMap& offline, const Pose& camera_from_place);
+
+// Adds places at other shifts, up to six in all; opposite shifts are the same.
+void add_look_alikes(std::span<const LookAlikePlace> more, std::vector<LookAlikePlace>& places);
 
 }  // namespace byre

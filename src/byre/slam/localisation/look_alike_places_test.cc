@@ -39,5 +39,15 @@ TEST(PlacesAlikeInOneRoom, AreEmpty) {
   EXPECT_THAT(look_alike_places(*offline_map_of(mission), true_camera_from_world(mission, 0)), IsEmpty());
 }
 
+TEST(LookAlikePlaces, AreAddedAtOtherShiftsUpToSix) {
+  const auto at = [](double x) { return LookAlikePlace{{x, 0.0, 0.0}, {}}; };
+  std::vector<LookAlikePlace> places = {at(5.0)};
+  add_look_alikes(std::vector{at(5.5), at(-5.0), at(10.0)}, places);
+  ASSERT_THAT(places, SizeIs(2)) << "the opposite shift is tested as well";
+  EXPECT_EQ(places[1].shift.x(), 10.0);
+  add_look_alikes(std::vector{at(2.0), at(13.0), at(16.0), at(19.0), at(22.0), at(25.0)}, places);
+  EXPECT_THAT(places, SizeIs(6));
+}
+
 }  // namespace
 }  // namespace byre

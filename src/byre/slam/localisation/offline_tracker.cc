@@ -19,12 +19,6 @@ bool is_certain(const PoseFilter& pose_filter) {
   return place.is_accepted() && place.log_odds() >= 0.0 && !place.is_contradicted_by_tag();
 }
 
-// Same shift, or the opposite one.
-bool is_about(const LookAlikePlace& one, const LookAlikePlace& other) {
-  constexpr double kSame = 1.0;  // metres
-  return std::min((one.shift - other.shift).norm(), (one.shift + other.shift).norm()) <= kSame;
-}
-
 // Shifts to the look-alike place and to the one on the other side, where the building may repeat beyond the map.
 std::array<Eigen::Vector3d, 2> both_ways(const LookAlikePlace& place) {
   return {place.shift, -place.shift};
@@ -224,26 +218,14 @@ double OfflineTracker::log_odds_of_path(const Pose& rival_from_place, const Mapp
 }
 
 std::span<const LookAlikePlace> OfflineTracker::look_alikes_at(const Pose& camera_from_place) {
-  constexpr std::size_t kMost = 6;  // bounds the time of a frame
   ScratchVector<KeyframeId> keyframes = keyframes_of_place(*offline_, camera_from_place);
   if (keyframes != keyframes_of_look_alikes_) {
-    const std::vector<LookAlikePlace> before =
-        std::exchange(look_alikes_, look_alike_places(*offline_, camera_from_place));
+    const auto before = std::exchange(look_alikes_, look_alike_places(*offline_, camera_from_place));
     present_look_alikes_ = look_alikes_.size();
-    for (const LookAlikePlace& place : before) {
-      const auto is_same = [&](const LookAlikePlace& known) { return is_about(known, place); };
-      if (look_alikes_.size() < kMost && std::ranges::none_of(look_alikes_, is_same)) {
-        look_alikes_.push_back(place);
-      }
-    }
+    add_look_alikes(before, look_alikes_);
     keyframes_of_look_alikes_ = std::move(keyframes);
   }
   return look_alikes_;
-}
-
-// The robot may be at a look-alike place, but frames cannot be tested there: no keyframe has this viewing direction.
-bool OfflineTracker::is_untestable(const Pose& camera_from_look_alike) const {
-  return keyframes_of_place(*offline_, camera_from_look_alike).empty();
 }
 
 // Points of a place, ascending, that may be those of a look-alike place: by their descriptors, or by features of the
@@ -255,7 +237,8 @@ std::vector<PointId> OfflineTracker::points_in_common(const TrackedFrame& tracke
   for (const LookAlikePlace& place : look_alikes_at(camera_from_place)) {
     for (const Eigen::Vector3d& shift : both_ways(place)) {
       const Pose camera_from_look_alike = camera_at(shift, camera_from_place);
-      const bool cannot_be_tested = is_untestable(camera_from_look_alike);
+      // The robot may be there, but no keyframe has this viewing direction.
+      const bool cannot_be_tested = keyframes_of_place(*offline_, camera_from_look_alike).empty();
       if (!cannot_be_tested && !rivals_.has_at(camera_from_place, camera_from_look_alike)) continue;
       untestable_ += cannot_be_tested;
       in_common.insert(in_common.end(), place.repeated.begin(), place.repeated.end());

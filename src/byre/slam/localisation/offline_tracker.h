@@ -142,10 +142,9 @@ class OfflineTracker {
   // features: receives the features tracked there.
   RivalPlaces::View view_at_rival(const Frame& frame, const Pose& predicted, const Rig& rig, const ImageMask& hidden,
                                   std::vector<int>* features = nullptr) const;
-  // Look-alikes of a place, and those of the places before it until one was certain: shifts at which a building repeats
-  // are not found from each of its places.
+  // Look-alikes of a place, and those of the places since the last certain one: a building repeats at a shift, but not
+  // each of its places has enough points that do.
   std::span<const LookAlikePlace> look_alikes_at(const Pose& camera_from_place);
-  bool is_untestable(const Pose& camera_from_look_alike) const;
   std::vector<PointId> points_in_common(const TrackedFrame& tracked);
   void propose_rivals(Timestamp time, const Pose& camera_from_place, std::span<const Pose> rivals, const Rig& rig,
                       const PoseFilter& pose_filter, const Mapper& mapper);
@@ -171,7 +170,7 @@ class OfflineTracker {
   ScratchVector<KeyframeId> keyframes_of_look_alikes_;  // keyframes of the last place that was not accepted
   std::vector<int> features_at_rivals_;                 // features of the frame that were tracked at rivals, ascending
   std::vector<LookAlikePlace> look_alikes_;             // see look_alikes_at()
-  std::size_t present_look_alikes_ = 0;                 // look-alikes of that place itself, the first ones
+  std::size_t present_look_alikes_ = 0;                 // number of that place's own look-alikes, the first ones
   int untestable_ = 0;                                  // look-alike places of the last view_of that cannot be tested
   bool shows_tag_ = false;                              // whether an agreeing tag is in that view
   int frames_since_rivals_ = 0;

@@ -249,6 +249,19 @@ TEST_F(OfflineTrackerInTwinRooms, ALookAlikeBeyondTheMapIsARival) {
   EXPECT_GT(tracker_.log_odds_of_rivals(), 1.9);
 }
 
+// From a place without keyframes nearby no look-alikes are found.
+TEST_F(OfflineTrackerInTwinRooms, ALookAlikeIsKeptUntilAPlaceIsCertain) {
+  const Pose seen = track_.tracked.camera_from_world;
+  track_.tracked.camera_from_world = seen * Pose{Eigen::Quaterniond::Identity(), {0.0, 0.0, 5.0}};
+  points_alone(true);
+  ASSERT_EQ(tracker_.log_odds_of_rivals(), kNoRivals);
+  track_.tracked.camera_from_world = seen;
+  points_alone(true);
+  track_.tracked.camera_from_world = seen * Pose{Eigen::Quaterniond::Identity(), {0.0, 0.0, 5.0}};
+  points_alone(true);
+  EXPECT_GT(tracker_.log_odds_of_rivals(), 1.9);
+}
+
 TEST_F(OfflineTrackerInTwinRooms, CommonPointsAreNoEvidenceAgainstARival) {
   EXPECT_EQ(points_alone(true), 0) << "a third room may look alike beyond the map";
   tracker_.begin_place(mission_.frames[0].time, track_.tracked.camera_from_world);
